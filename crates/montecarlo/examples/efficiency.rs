@@ -92,7 +92,8 @@ fn reductions(ground: &Ground) -> Result<(), Box<dyn Error>> {
     for points in [PointSet::Independent, PointSet::Jittered, PointSet::NRooks, PointSet::MultiJittered] {
         println!("  {:28} {:.2}", points.name(), ratio(path(all), points));
     }
-    let control = Control::new(&ground.scene, mean.clone(), false)?;
+    let shares: Vec<f64> = (0..ground.scene.len()).map(|patch| ground.scene.exposed(patch)).collect();
+    let control = Control::new(&ground.scene, (mean.clone(), &shares), false)?;
     let shooting = ResidualShooting::new(&ground.scene, control, all);
     let shooting =
         shooting.shared_out(&ground.scene, &ground.groups()?, (5, PointSet::Sobol), &fredholm_linop::Quiet);

@@ -64,6 +64,12 @@ impl Groups {
         self.levels[0].areas[self.levels[0].of[patch]]
     }
 
+    /// Mean area of the groups of the first level, m².
+    pub(crate) fn mean_area(&self) -> f64 {
+        let areas = &self.levels[0].areas;
+        areas.iter().sum::<f64>() / areas.len() as f64
+    }
+
     /// Areas of the groups of all levels, m².
     fn areas(&self) -> Vec<f64> {
         self.levels.iter().flat_map(|level| level.areas.iter().copied()).collect()

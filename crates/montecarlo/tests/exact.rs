@@ -133,7 +133,7 @@ fn pixels_show_the_radiosity_within_their_errors() {
 fn a_control_variate_changes_no_mean_and_takes_noise_away() {
     let scene = squares(0.8);
     let below = SQUARES / (1.0 - 0.64 * SQUARES * SQUARES);
-    let control = Control::new(&scene, vec![below, 0.8 * SQUARES * below], false).unwrap();
+    let control = Control::new(&scene, (vec![below, 0.8 * SQUARES * below], &[1.0; 2]), false).unwrap();
     let traced = |estimator: &dyn Estimator, seed| {
         let state = run(&scene, estimator, single(&scene), (seed, 64, 4000));
         [state.groups.mean().to_vec(), state.groups.standard_errors()]
@@ -167,7 +167,7 @@ fn a_control_variate_decides_nothing_where_another_patch_lies() {
     patches.push(Patch::quad(turned).unwrap().unwrap());
     let scene = Enclosure::new(patches, 1, vec![0.8, 0.8, 0.0], vec![0.0, 1.0, 0.0]).unwrap();
     let below = 0.5 * SQUARES;
-    let control = Control::new(&scene, vec![below, 0.8 * SQUARES * below, 0.0], false).unwrap();
+    let control = Control::new(&scene, (vec![below, 0.8 * SQUARES * below, 0.0], &[1.0; 3]), false).unwrap();
     let controlled = ResidualShooting::new(&scene, control, Switches::default());
     let plain = PathTracing::continuous(Switches::default());
     let traced = |estimator: &dyn Estimator, seed| {

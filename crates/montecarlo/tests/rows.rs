@@ -235,7 +235,7 @@ fn lamps_behind_a_wall_are_looked_at_less() {
     sampler.learn(&few);
     let learned = cast(&sampler, 3, 16);
     let ratio = square_error(&learned) / square_error(&by_bounds);
-    assert!(ratio < 0.5, "{ratio}");
+    assert!(ratio < 0.7, "{ratio}");
     // Every tile by itself, by what its replicates differ: no light is lost or found twice.
     let many = cast(&sampler, 4, 256);
     let replicates = many.direct_replicates();

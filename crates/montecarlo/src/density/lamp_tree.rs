@@ -247,11 +247,14 @@ impl LampTree {
             );
             large.sort_unstable_by(|a, b| b.total_cmp(a));
             large.truncate(MOST_PARTS.saturating_sub(parts.len()));
-            let Some(&least) = large.last() else { break };
+            let (Some(&least), mut left) = (large.last(), large.len()) else { break };
             opened.clear();
             for &whole in parts.iter() {
-                match second(&whole).filter(|_| whole.most >= least) {
-                    Some(second) => opened.extend([part(whole.node + 1), part(second)].into_iter().flatten()),
+                match second(&whole).filter(|_| whole.most >= least && left > 0) {
+                    Some(second) => {
+                        opened.extend([part(whole.node + 1), part(second)].into_iter().flatten());
+                        left -= 1;
+                    }
                     None => opened.push(whole),
                 }
             }
@@ -338,7 +341,7 @@ impl LampTree {
     }
 
     /// The place of a lamp in the order of the tree; none of other patches.
-    pub(super) fn place(&self, patch: usize) -> Option<u32> {
+    pub(crate) fn place(&self, patch: usize) -> Option<u32> {
         self.place_of[patch]
     }
 

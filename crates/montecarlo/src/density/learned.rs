@@ -1,9 +1,10 @@
 //! Lamps in proportion to what looks at them have found.
 //!
 //! A bound on what a lamp brings knows nothing of what stands between. Looks do: each of them is an
-//! estimate y = M κ V/p_L of what all lamps bring to its receiver. Of all ways to choose between the
-//! parts of a cut, the one with probabilities in proportion to P √⟨y²⟩ has the least variance, where
-//! P are those by which looks were chosen and the mean is over looks at a part. Receivers near each
+//! estimate y = M κ V/p_L of what all lamps bring to its receiver, less where a ray may find the lamp
+//! too. Of all ways to choose between the parts of a cut, the one with probabilities in proportion to
+//! P √⟨y²⟩ has the least variance, where P are those by which looks were chosen and the mean is over
+//! looks at a part; where rays count too, it is near that. Receivers near each
 //! other that face the same way have much in common: so the mean is that of x = y/Σ bound over a
 //! small group of them, and over a large one where few looks are known (after P. Vévoda,
 //! I. Kondapaneni, J. Křivánek, *Bayesian online regression for adaptive direct illumination
@@ -24,14 +25,13 @@ const PRIOR_LOOKS: f32 = 2.0;
 
 /// A look at a lamp.
 #[derive(Clone, Copy, Debug)]
-pub struct Look {
+pub(crate) struct Look {
     /// From which receiver.
-    pub receiver: u32,
-    /// At which patch.
-    pub patch: u32,
-    /// The estimate of what all lamps bring, M κ V over its density, over the sum of the receiver's
-    /// bounds.
-    pub found: f32,
+    pub(crate) receiver: u32,
+    /// At which lamp, by its place in the order of the tree.
+    pub(crate) place: u32,
+    /// The estimate of what all lamps bring, over the sum of the receiver's bounds.
+    pub(crate) found: f32,
 }
 
 /// Receivers near each other that face the same way.
@@ -63,12 +63,13 @@ impl Found {
     fn new(looks: &[Seen], group_of: &[u32], groups: usize) -> Self {
         let mut found = Self { starts: vec![0], seen: Vec::new() };
         let (starts, order) = sorted(group_of, groups);
+        let place = |look: u32| looks[look as usize].place;
         for range in starts.windows(2) {
-            let own = order[range[0]..range[1]].chunk_by(|&a, &b| looks[a].place == looks[b].place);
+            let own = order[range[0]..range[1]].chunk_by(|&a, &b| place(a) == place(b));
             found.seen.extend(own.map(|same| Seen {
-                place: looks[same[0]].place,
+                place: place(same[0]),
                 looks: same.len() as f32,
-                squares: same.iter().map(|&look| looks[look].squares).sum(),
+                squares: same.iter().map(|&look| looks[look as usize].squares).sum(),
             }));
             found.starts.push(found.seen.len());
         }
@@ -82,7 +83,7 @@ impl Found {
 
 /// The numbers of things in the order of their kinds, in that which they have within each, and where
 /// those of each kind begin and those of the last end.
-fn sorted(kinds: &[u32], count: usize) -> (Vec<usize>, Vec<usize>) {
+fn sorted(kinds: &[u32], count: usize) -> (Vec<usize>, Vec<u32>) {
     let mut starts = vec![0; count + 1];
     for &kind in kinds {
         starts[kind as usize + 1] += 1;
@@ -91,7 +92,7 @@ fn sorted(kinds: &[u32], count: usize) -> (Vec<usize>, Vec<usize>) {
         starts[kind + 1] += starts[kind];
     }
     let (mut next, mut order) = (starts.clone(), vec![0; kinds.len()]);
-    for (thing, &kind) in kinds.iter().enumerate() {
+    for (thing, &kind) in (0..).zip(kinds) {
         order[next[kind as usize]] = thing;
         next[kind as usize] += 1;
     }
@@ -108,7 +109,7 @@ fn mean(seen: &[Seen], (begin, end): (u32, u32), prior: f32) -> f32 {
 
 impl Cuts {
     /// Chooses lamps by what looks have found, which these cuts have chosen.
-    pub fn learn(&mut self, tree: &LampTree, receivers: &[Receiver], looks: &[Look]) {
+    pub(crate) fn learn(&mut self, tree: &LampTree, receivers: &[Receiver], looks: &[Look]) {
         let groups = Groups::new(receivers, looks);
         let [small, large] = groups.found(tree, looks);
         let (members, order) = sorted(&groups.small_of, groups.large_of.len());
@@ -119,7 +120,7 @@ impl Cuts {
             let whole = mean(far, (0, u32::MAX), 0.0);
             // A group to which no look found any light may yet have some.
             for &receiver in order[range[0]..range[1]].iter().filter(|_| whole > 0.0) {
-                self.reweigh(receiver, |part| {
+                self.reweigh(receiver as usize, |part| {
                     let (by, root) = &mut known[part as usize];
                     if *by != group {
                         let places = tree.places(part);
@@ -200,14 +201,14 @@ impl Groups {
     /// What looks have found from the small groups, and from the large ones.
     fn found(&self, tree: &LampTree, looks: &[Look]) -> [Found; 2] {
         // In the order of the tree, and where two are at one lamp, in that in which they were made.
-        let places: Vec<u32> = looks.iter().filter_map(|look| tree.place(look.patch as usize)).collect();
+        let places: Vec<u32> = looks.iter().map(|look| look.place).collect();
         let (_, order) = sorted(&places, tree.lamps());
-        let look = |&look: &usize| {
-            let found = looks[look].found;
-            Seen { place: places[look], looks: 1.0, squares: found * found }
+        let look = |&look: &u32| {
+            let Look { place, found, .. } = looks[look as usize];
+            Seen { place, looks: 1.0, squares: found * found }
         };
         let seen: Vec<Seen> = order.iter().map(look).collect();
-        let small_of = |&look: &usize| self.small_of[looks[look].receiver as usize];
+        let small_of = |&look: &u32| self.small_of[looks[look as usize].receiver as usize];
         let small_of: Vec<u32> = order.iter().map(small_of).collect();
         let large_of: Vec<u32> = small_of.iter().map(|&small| self.large_of[small as usize]).collect();
         let large_groups = self.large_of.last().map_or(0, |&last| last as usize + 1);

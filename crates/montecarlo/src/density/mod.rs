@@ -16,7 +16,7 @@ pub use cosine::Cosine;
 pub use frame::Frame;
 pub use lamp_tree::{Cut, Cuts, LampTree, Receiver};
 pub use lamps::LampDensity;
-pub use learned::Look;
+pub(crate) use learned::Look;
 pub use surface::SurfaceDensity;
 pub use uniform::{UniformHemisphere, UniformSphere};
 pub use von_mises_fisher::VonMisesFisher;

@@ -7,7 +7,7 @@
 //!
 //! | method | estimates | roulette | next event | multiple importance | control |
 //! |---|---|---|---|---|---|
-//! | `path` | the continuous equation, from the patches | yes | yes | yes | yes |
+//! | `path` | the continuous equation, from the patches | yes | yes | yes | [`ResidualShooting`] |
 //! | `light` | the continuous equation, from the lamps | yes | | | |
 //! | `bidirectional` | the continuous equation, from both | yes | | always | |
 //! | `photon` | the continuous equation, with a bias that vanishes with the batches | yes | yes | yes | |

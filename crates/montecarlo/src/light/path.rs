@@ -21,12 +21,13 @@ use crate::locator::overlaid;
 use crate::points::Draw;
 use crate::{Enclosure, MonteCarloError, Site};
 use std::f64::consts::FRAC_1_PI;
+use std::sync::Arc;
 
 /// Path tracing from patches, or a gathering walk where it is patch-wise.
 pub struct PathTracing {
     switches: Switches,
     patchwise: bool,
-    control: Option<Control>,
+    control: Option<Arc<Control>>,
     directions: Box<dyn DirectionDensity>,
 }
 
@@ -41,22 +42,31 @@ pub struct Control {
 }
 
 impl Control {
-    /// Irradiances of the patches (W/m², means over the whole, patch-major).
+    /// Irradiances of the patches (W/m², means over the whole, patch-major), which stand for the
+    /// exposed shares that the solution has taken.
     ///
     /// # Errors
     /// [`MonteCarloError::Length`].
-    pub fn new(scene: &Enclosure, irradiance: Vec<f64>, patchwise: bool) -> Result<Self, MonteCarloError> {
+    pub fn new(
+        scene: &Enclosure,
+        (irradiance, exposed): (Vec<f64>, &[f64]),
+        patchwise: bool,
+    ) -> Result<Self, MonteCarloError> {
         let (bands, expected) = (scene.bands(), scene.len() * scene.bands());
         if irradiance.len() != expected {
             let found = irradiance.len();
             return Err(MonteCarloError::Length { what: "the control variate", expected, found });
         }
-        let share = |at: usize| if patchwise { 1.0 } else { scene.exposed(at / bands) };
+        if exposed.len() != scene.len() {
+            let (expected, found) = (scene.len(), exposed.len());
+            return Err(MonteCarloError::Length { what: "the list of exposed shares", expected, found });
+        }
+        let share = |at: usize| if patchwise { 1.0 } else { exposed[at / bands] };
         let met = |(at, e): (usize, &f64)| if share(at) > 0.0 { e / share(at) } else { 0.0 };
         let bare = overlaid(scene.patches()).into_iter().enumerate();
         Ok(Self {
             met: irradiance.iter().enumerate().map(met).collect(),
-            known: bare.map(|(patch, overlaid)| !overlaid && scene.exposed(patch) >= 1.0).collect(),
+            known: bare.map(|(patch, overlaid)| !overlaid && exposed[patch] >= 1.0).collect(),
             whole: irradiance,
         })
     }
@@ -93,8 +103,8 @@ impl PathTracing {
 
     /// The same with a control variate.
     #[must_use]
-    pub fn with_control(self, control: Control) -> Self {
-        Self { control: Some(control), ..self }
+    pub fn with_control(self, control: impl Into<Arc<Control>>) -> Self {
+        Self { control: Some(control.into()), ..self }
     }
 
     /// The same with another density of directions than the cosine.

@@ -12,8 +12,8 @@
 //! over its patch, as a solution makes it, r has the mean 0: it is the estimate at a point less the
 //! mean of those at other points of the patch, by the same lamps and directions, so that what they
 //! have in common, which is most of the noise, is gone. The result is then as exact as the form
-//! factors behind Ẽ. Of patches on which another one lies that mean is not known, since rays that
-//! start under it meet what no light comes from: there r is the estimate less Ẽ, and E_i the mean of
+//! factors behind Ẽ. Of patches on which another one lies that mean is not known, since it depends on
+//! how much of them is covered, to the last digit: there r is the estimate less Ẽ, and E_i the mean of
 //! the estimates and what arrives.
 //!
 //! The estimate at a point takes half of the rays that leave it and is sent along the other half, so
@@ -29,6 +29,7 @@ use crate::points::{Draw, PointSet, Samples};
 use crate::{Enclosure, Groups, Site};
 use fredholm_linop::Watch;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Sets of points of a patch, the one to be compared with the other, and halves of the rays of each
 /// point.
@@ -43,14 +44,15 @@ const TRIAL_BATCHES: u32 = 4;
 const TRIAL_SEED: u64 = 0x5bd1_e995_0000_0000;
 /// Share of the points that are shared out evenly, since a trial may miss what varies.
 const EVEN: f64 = 0.25;
-/// Most points of a set over their mean.
-const MOST_POINTS: f64 = 64.0;
+/// Most points of a set: what their rays find is held at once.
+const MOST_POINTS: f64 = 4096.0;
 
-/// Particles that carry what a solution has missed.
+/// Particles that carry what a solution has missed. They are reflected as often as it may be, since
+/// the solution has all reflections.
 pub struct ResidualShooting {
     switches: Switches,
     paths: PathTracing,
-    control: Control,
+    control: Arc<Control>,
     /// Points of a set of each patch over the mean of all.
     shares: Vec<f64>,
 }
@@ -76,12 +78,14 @@ impl ResidualShooting {
     /// Shoots what these irradiances have missed, with as many points of every patch.
     #[must_use]
     pub fn new(scene: &Enclosure, control: Control, switches: Switches) -> Self {
-        let paths = PathTracing::continuous(switches).with_control(control.clone());
+        let control = Arc::new(control);
+        let paths = PathTracing::continuous(switches).with_control(Arc::clone(&control));
         Self { switches, paths, control, shares: vec![1.0; scene.len()] }
     }
 
-    /// The same with the points shared out so that the means of groups have the least error in L²,
-    /// by what a trial finds; evenly where the watch breaks it off.
+    /// The same with the points shared out by what a trial finds, so that the error of the means of
+    /// groups in L² is about the least; evenly where the watch breaks it off. What is sent counts as
+    /// if it arrived on a mean group.
     #[must_use]
     pub fn shared_out(
         self,
@@ -104,19 +108,17 @@ impl ResidualShooting {
                 };
                 let sent = of(&rays.missed(known), &|band| rho[band]);
                 let own = known.map_or(0.0, |_| of(&rays.missed(None), &|_| 1.0));
-                Some(sent + own)
+                Some(sent / groups.mean_area() + own / groups.area_of(patch))
             };
-            (0..scene.len()).map(square).collect()
+            (0..scene.len()).into_par_iter().map(square).collect()
         };
-        let Some(found): Option<Vec<Vec<f64>>> = (0..TRIAL_BATCHES).into_par_iter().map(trial).collect()
-        else {
+        let Some(found): Option<Vec<Vec<f64>>> = (0..TRIAL_BATCHES).map(trial).collect() else {
             return self;
         };
         let noise: Vec<f64> = (0..scene.len())
             .map(|patch| {
                 let square = found.iter().map(|of_batch| of_batch[patch]).sum::<f64>();
-                let area = scene.patches()[patch].area();
-                area * (square / groups.area_of(patch)).sqrt()
+                scene.patches()[patch].area() * square.sqrt()
             })
             .collect();
         let mean = noise.iter().sum::<f64>() / noise.len() as f64;
@@ -127,7 +129,7 @@ impl ResidualShooting {
     /// Points of a set of a patch in a batch.
     fn size(&self, batch: &Batch, patch: usize) -> u32 {
         let mean = f64::from(batch.samples) / (f64::from(RAYS) * (SETS * HALVES) as f64);
-        1 << (mean * self.shares[patch].min(MOST_POINTS)).max(1.0).log2().round() as u32
+        1 << (mean * self.shares[patch]).clamp(1.0, MOST_POINTS).log2().round() as u32
     }
 
     /// What r is compared with where the solution is not known to be the mean over its patch.
@@ -222,7 +224,7 @@ fn mean(rows: &[f64], bands: usize, band: usize) -> f64 {
 
 impl Estimator for ResidualShooting {
     fn name(&self) -> &'static str {
-        "path"
+        "residual-shooting"
     }
 
     fn gathers(&self) -> bool {
@@ -234,14 +236,17 @@ impl Estimator for ResidualShooting {
         let mut work = Work::default();
         out.fill(0.0);
         let mut power = vec![0.0; bands];
-        let mut means = Vec::with_capacity(out.len());
+        let mut means = Vec::new();
         for patch in 0..scene.len() {
+            if self.control.knows(patch) && scene.reflectance(patch).iter().all(|&rho| rho == 0.0) {
+                // It sends nothing on.
+                continue;
+            }
             let mut rays = self.rays(scene, batch, (patch, self.size(batch, patch)));
             work += Work { paths: rays.met.len() as u64, rays: rays.traced };
             let known = self.known(scene, patch);
-            match known {
-                None => means.extend_from_slice(self.control.whole_at(scene, patch)),
-                Some(_) => means.extend((0..bands).map(|band| mean(&rays.found, bands, band))),
+            if known.is_some() {
+                means.extend((0..bands).map(|band| mean(&rays.found, bands, band)));
             }
             let missed = rays.missed(known);
             let (rho, points) = (scene.reflectance(patch), rays.points.len());
@@ -254,6 +259,9 @@ impl Estimator for ResidualShooting {
                         let &Some((site, factor)) = arrived else { continue };
                         let sent = power.iter_mut().zip(rho).zip(missed);
                         sent.for_each(|((power, rho), missed)| *power = rho * missed * factor * share);
+                        if power.iter().all(|&power| power == 0.0) {
+                            continue;
+                        }
                         let sample = if rays.is_paired { number } else { number * points as u32 + k };
                         let mut draw = samples.draw(sample);
                         // The numbers of the ray itself come first.
@@ -264,7 +272,12 @@ impl Estimator for ResidualShooting {
             }
         }
         per_area(scene, out);
-        out.iter_mut().zip(means).for_each(|(out, mean)| *out += mean);
+        let mut means = means.chunks(bands);
+        for (patch, row) in out.chunks_mut(bands).enumerate() {
+            let is_known = self.control.knows(patch);
+            let mean = if is_known { Some(self.control.whole_at(scene, patch)) } else { means.next() };
+            row.iter_mut().zip(mean.into_iter().flatten()).for_each(|(out, mean)| *out += mean);
+        }
         work
     }
 }

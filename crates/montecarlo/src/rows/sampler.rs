@@ -324,11 +324,11 @@ impl<'a> RowSampler<'a> {
             if is_seen {
                 add(sum, weight, share, exitance);
             }
-            if !self.has_learned {
+            if let Some(place) = self.lamps.place(patch).filter(|_| !self.has_learned) {
                 let receiver = self.ends[from.patch].family;
                 let mean = exitance.iter().sum::<f64>() / exitance.len() as f64;
                 let found = (share * mean / self.cuts.total(receiver as usize)) as f32;
-                looked.push(Look { receiver, patch: patch as u32, found });
+                looked.push(Look { receiver, place, found });
             }
         }
     }

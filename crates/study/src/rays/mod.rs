@@ -25,7 +25,7 @@ use std::sync::Arc;
 use fredholm_coupling::Means;
 use fredholm_linop::{MultiVector, StopReason};
 use fredholm_mesh::{Mesh, Patch};
-use fredholm_montecarlo::rows::{Family, Looks, RowSampler};
+use fredholm_montecarlo::rows::{Family, Looks, REPLICATES, RowSampler};
 use fredholm_scene::Scene;
 use fredholm_visibility::Occluders;
 
@@ -54,9 +54,6 @@ const OF_ELEMENTS: f64 = 0.6;
 const MOST_OF_ELEMENTS: f64 = 0.85;
 /// Error by chance over what the elements leave to it, up to which it is.
 const MOST_NOISE_OVER_WHAT_IS_LEFT: f64 = 1.3;
-/// Error by chance over what is left to it, so that the first rows are likely to be enough: lamps
-/// are chosen better than in the first step, which tells what rows vary by.
-const AIM: f64 = 1.0;
 /// Standard deviation of what a ray brings over its mean, about; share of all rays that the first
 /// step takes; and its rays of a part and replicate at most.
 const DEVIATION: f64 = 0.8;
@@ -84,6 +81,9 @@ const RAYS_OF_A_LARGE_FACE_ALONE: f64 = 5000.0;
 const RAYS_OF_FOUR_PARTS: f64 = 64.0;
 /// Bytes of a ray, twice while rows grow, and of a part and band of it.
 const BYTES_OF_A_RAY: f64 = 10.0;
+/// Bytes of a look at a lamp in the first step while lamps are weighed by it, and looks of a ray.
+const BYTES_OF_A_LOOK: f64 = 80.0;
+const LOOKS_OF_A_RAY: f64 = 2.0;
 const BYTES_OF_A_PART: u128 = 700;
 const BYTES_OF_A_BAND: u128 = 400;
 /// How to need less memory.
@@ -138,6 +138,12 @@ fn in_four(mesh: &Mesh, accuracy: f64) -> impl Iterator<Item = bool> {
     })
 }
 
+/// Rays of a part and replicate in the first step.
+fn rays_of_first_step(accuracy: f64) -> u32 {
+    let few = OF_FIRST_STEP * (DEVIATION / accuracy).powi(2) / 64.0;
+    1 << few.clamp(1.0, MOST_OF_FIRST_STEP).log2().round() as u32
+}
+
 /// Solves a scene to an accuracy.
 pub(crate) fn compute(
     scene: &Arc<Scene>,
@@ -147,7 +153,7 @@ pub(crate) fn compute(
 ) -> Result<(Problem, Solution), Error> {
     let limit = options.problem.memory_limit();
     let count = usize::try_from(scene.predicted_elements()).unwrap_or(usize::MAX);
-    stages.admit(&plan(scene, (count, 0.0), options), limit, HELP)?;
+    stages.admit(&plan(scene, (count, 0.0, accuracy), options), limit, HELP)?;
     let mut mesh = stages.run("mesh", || scene.mesh().map_err(scene_failure))?;
     let plan = plan_on(scene, &mesh, options, accuracy);
     stages.admit(&plan, limit, HELP)?;
@@ -173,17 +179,20 @@ pub(crate) fn expected_plan(scene: &Scene, options: &SolveSettings, accuracy: f6
 pub(crate) fn plan_on(scene: &Scene, mesh: &Mesh, options: &SolveSettings, accuracy: f64) -> Plan {
     let rays = expected(mesh.len() as f64, Faces::of(mesh), accuracy);
     let parts = mesh.len() + 3 * in_four(mesh, accuracy).filter(|&is_cut| is_cut).count();
-    plan(scene, (parts, rays), options)
+    plan(scene, (parts, rays, accuracy), options)
 }
 
-fn plan(scene: &Scene, (parts, rays): (usize, f64), options: &SolveSettings) -> Plan {
+fn plan(scene: &Scene, (parts, rays, accuracy): (usize, f64, f64), options: &SolveSettings) -> Plan {
     let count = parts as u128;
+    // Looks are forgotten before most rays are cast.
+    let first = (REPLICATES * parts) as f64 * f64::from(rays_of_first_step(accuracy));
+    let most = (BYTES_OF_A_RAY * rays).max((BYTES_OF_A_RAY + LOOKS_OF_A_RAY * BYTES_OF_A_LOOK) * first);
     let pictures = pictures(scene, 1, (options.no_pictures, options.further_pictures()));
     let bands = scene.bands().len() as u128;
     let rows = (BYTES_OF_A_PART + BYTES_OF_A_BAND * bands).saturating_mul(count);
     let plan = Plan::default()
         .hold(format!("{parts} parts of elements"), BYTES_OF_AN_ELEMENT.saturating_mul(count))
-        .stage("rays", rows.saturating_add((BYTES_OF_A_RAY * rays) as u128));
+        .stage("rays", rows.saturating_add(most as u128));
     with_results(plan, scene, parts, (pictures, 0))
 }
 
@@ -243,8 +252,7 @@ struct Run<'s> {
 impl Run<'_> {
     /// The steps on the parts of one mesh: which of them to divide; none where it is done.
     fn on(&mut self, ground: &Ground, everywhere: &mut bool) -> Result<Option<Vec<bool>>, Error> {
-        let few = OF_FIRST_STEP * (DEVIATION / self.accuracy).powi(2) / 64.0;
-        let few = 1 << few.clamp(1.0, MOST_OF_FIRST_STEP).log2().round() as u32;
+        let few = rays_of_first_step(self.accuracy);
         let first = ground.at_least(RAYS_OF_A_LARGE_FACE, &vec![few; ground.families.len()]);
         let mut sampler = RowSampler::new(&ground.lit, &ground.families, SEED);
         let (mut budget, mut known) = (None, Known::default());
@@ -356,7 +364,7 @@ impl Run<'_> {
 
     /// The error by chance that an error of the elements leaves.
     fn left(&self, elements: f64) -> f64 {
-        AIM * (self.accuracy.powi(2) - elements.powi(2)).max(0.0).sqrt()
+        (self.accuracy.powi(2) - elements.powi(2)).max(0.0).sqrt()
     }
 
     /// The rays that are likely to be enough, from the first step.

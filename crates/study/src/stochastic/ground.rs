@@ -9,7 +9,7 @@ use fredholm_montecarlo::{Enclosure, Groups, Surfaces};
 use fredholm_scene::Scene;
 
 use super::tracer::failure;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind};
 use crate::memory::{self, Plan};
 use crate::options::{ProblemOptions, SceneSource, USUAL_DISCRETISATION};
 use crate::prediction::BYTES_OF_AN_ELEMENT;
@@ -21,7 +21,7 @@ use crate::stages::Stages;
 /// is written.
 const BYTES_OF_A_TRACED_ELEMENT: u128 = 600;
 /// Vectors of all elements and bands held at once: a wave of batches, sums, means and errors.
-const VECTORS_HELD: u128 = fredholm_montecarlo::BATCHES_AT_ONCE as u128 + 10;
+const VECTORS_HELD: u128 = fredholm_montecarlo::BATCHES_AT_ONCE as u128 + 12;
 
 /// Bytes of an element while the results are drawn and written, and of each of its values: what
 /// paths are traced on is still there.
@@ -95,25 +95,26 @@ pub(crate) fn faces(mesh: &Mesh, enclosure: &Enclosure) -> Result<Groups, Error>
     Groups::new(enclosure, of, mesh.faces().len()).map_err(failure)
 }
 
-/// A problem whose solution is to be a control variate, for constants on the elements whatever the
-/// scene asks for: of them alone it is known that they are the means of what they send.
+/// A problem whose solution is to be a control variate: constants on the elements, whatever the
+/// scene asks for, since of them alone it is known that they are the means of what they send.
 pub(crate) fn controlling(
     source: &SceneSource,
     asked: &ProblemOptions,
     more: &dyn Fn(Plan, &Scene, usize) -> Plan,
     stages: &mut Stages,
 ) -> Result<Problem, Error> {
-    let usual = || USUAL_DISCRETISATION.to_owned();
-    let discretisation = Some(asked.discretisation.clone().unwrap_or_else(usual));
-    let asked = ProblemOptions { discretisation, ..asked.clone() };
-    let problem = Problem::load(source, &asked, more, stages)?;
-    problem.require_radiosity("a control variate")?;
-    Ok(problem)
+    if let Some(other) = asked.discretisation.as_ref().filter(|&name| name != USUAL_DISCRETISATION) {
+        let text = format!("a control variate is the solution by {USUAL_DISCRETISATION}, not by {other}");
+        return Err(Error::new(ErrorKind::Input, text).with_help("leave out --discretisation"));
+    }
+    let asked = ProblemOptions { discretisation: Some(USUAL_DISCRETISATION.to_owned()), ..asked.clone() };
+    Problem::load(source, &asked, more, stages)
 }
 
 /// A deterministic solution as a control variate.
 pub(crate) fn control(enclosure: &Enclosure, solution: &Solution, patchwise: bool) -> Result<Control, Error> {
-    Control::new(enclosure, solution.means.irradiance.as_slice().to_vec(), patchwise).map_err(failure)
+    let irradiance = solution.means.irradiance.as_slice().to_vec();
+    Control::new(enclosure, (irradiance, &solution.exposed), patchwise).map_err(failure)
 }
 
 /// What a deterministic solution says of the error of the irradiance of each face and band, W/m²:
