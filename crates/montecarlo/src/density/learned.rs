@@ -1,13 +1,13 @@
 //! Lamps in proportion to what looks at them have found.
 //!
 //! A bound on what a lamp brings knows nothing of what stands between. Looks do: each of them is an
-//! estimate y = M κ V/p_L of what all lamps bring to its receiver, less where a ray may find the lamp
-//! too. Of all ways to choose between the parts of a cut, the one with probabilities in proportion to
-//! P √⟨y²⟩ has the least variance, where P are those by which looks were chosen and the mean is over
-//! looks at a part; where rays count too, it is near that. Receivers near each
+//! estimate y = M κ V/p_L of what all lamps bring to its receiver, less where a ray may find the
+//! lamp too. Of all ways to choose between the parts of a cut, the one with probabilities in
+//! proportion to P √⟨y²⟩ has the least variance, where P are those by which looks were chosen and
+//! the mean is over looks at a part; where rays count too, it is near that. Receivers near each
 //! other that face the same way have much in common: so the mean is that of x = y/Σ bound over a
-//! small group of them, and over a large one where few looks are known (after P. Vévoda,
-//! I. Kondapaneni, J. Křivánek, *Bayesian online regression for adaptive direct illumination
+//! small group of them, and over a large one where few looks are known (after P. Vévoda, I.
+//! Kondapaneni, J. Křivánek, *Bayesian online regression for adaptive direct illumination
 //! sampling*, ACM Trans. Graph. 37(4), 2018, doi:10.1145/3197517.3201340). A share of [`BY_BOUND`]
 //! stays with the bounds, since no lamp that may light a receiver may be left out.
 

@@ -156,7 +156,7 @@ impl ResidualShooting {
         for (samples, found) in halves.iter_mut().zip(found.chunks_mut(points.len() * bands)) {
             for number in 0..RAYS {
                 for ((k, &point), found) in (0..).zip(&points).zip(found.chunks_mut(bands)) {
-                    let sample = if is_paired { number } else { number * points.len() as u32 + k };
+                    let sample = sample(is_paired, number, (k, points.len()));
                     let numbers = self.numbers(&mut samples.draw(sample));
                     let left = self.paths.leave(scene, (point, 0, true), &numbers, &weight, found);
                     traced += left.rays;
@@ -217,6 +217,11 @@ impl Rays<'_> {
     }
 }
 
+/// Which sample of a half has the numbers of a ray of the k-th of so many points.
+fn sample(is_paired: bool, number: u32, (k, points): (u32, usize)) -> u32 {
+    if is_paired { number } else { number * points as u32 + k }
+}
+
 /// Mean of a band.
 fn mean(rows: &[f64], bands: usize, band: usize) -> f64 {
     rows.iter().skip(band).step_by(bands).sum::<f64>() / (rows.len() / bands) as f64
@@ -262,7 +267,7 @@ impl Estimator for ResidualShooting {
                         if power.iter().all(|&power| power == 0.0) {
                             continue;
                         }
-                        let sample = if rays.is_paired { number } else { number * points as u32 + k };
+                        let sample = sample(rays.is_paired, number, (k, points));
                         let mut draw = samples.draw(sample);
                         // The numbers of the ray itself come first.
                         self.numbers(&mut draw);
